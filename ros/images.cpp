@@ -73,6 +73,19 @@ constexpr ColorLayout kColorLayouts[] = {{"rgb8", CV_8UC3, -1},
                                          {"mono8", CV_8UC1, cv::COLOR_GRAY2RGB},
                                          {"mono16", CV_16UC1, cv::COLOR_GRAY2RGB}};
 
+/// Of a grey image of 10 to 16 bits, the highest eight that its brightest pixel has.
+cv::Mat eight_bits(const cv::Mat& grey, bool big_endian) {
+  cv::Mat bytes[2], out;
+  cv::split(cv::Mat(grey.size(), CV_8UC2, grey.data, grey.step), bytes);
+  if (big_endian) std::swap(bytes[0], bytes[1]);
+  double high = 0;
+  cv::minMaxLoc(bytes[1], nullptr, &high);
+  if (high == 0) return bytes[0];
+  const int shift = std::bit_width(static_cast<unsigned>(high));  // of 256 to 65535
+  cv::addWeighted(bytes[1], std::ldexp(1, 8 - shift), bytes[0], std::ldexp(1, -shift), 0, out);
+  return out;
+}
+
 }  // namespace
 
 Status check_size(const std::string& what, std::uint32_t width, std::uint32_t height) {
@@ -101,10 +114,7 @@ Result<std::vector<std::uint8_t>> color_from_image(const ImageView& image) {
     if (!step.ok()) return step.status();
     const cv::Size size(static_cast<int>(image.width), static_cast<int>(image.height));
     cv::Mat pixels(size, layout.type, const_cast<std::uint8_t*>(image.data), *step);
-    if (pixels.depth() == CV_16U) {  // its higher bytes
-      cv::extractChannel(cv::Mat(size, CV_8UC2, pixels.data, *step), pixels,
-                         image.big_endian ? 0 : 1);
-    }
+    if (pixels.depth() == CV_16U) pixels = eight_bits(pixels, image.big_endian);
     std::vector<std::uint8_t> rgb(std::size_t{3} * image.width * image.height);
     cv::Mat out(size, CV_8UC3, rgb.data());
     if (layout.to_rgb < 0) {

@@ -95,8 +95,30 @@ INSTANTIATE_TEST_SUITE_P(Encodings, Color,
                                          ColorCase{"rgba8", {1, 2, 3, 9}, {1, 2, 3}},
                                          ColorCase{"bgra8", {3, 2, 1, 9}, {1, 2, 3}},
                                          ColorCase{"mono8", {7}, {7, 7, 7}},
-                                         ColorCase{"mono16", {200, 7}, {7, 7, 7}}),
+                                         ColorCase{"mono16", {200, 7}, {249, 249, 249}}),
                          [](const auto& test) { return test.param.encoding; });
+
+/// Cameras have 10 to 16 bits, and say so nowhere.
+TEST(Mono16, HasTheHighestEightBitsThatAreUsed) {
+  const auto greys = [](std::vector<std::uint16_t> values, bool big_endian) {
+    std::vector<std::uint8_t> bytes;
+    for (const std::uint16_t value : values) {
+      bytes.push_back(static_cast<std::uint8_t>(big_endian ? value >> 8 : value));
+      bytes.push_back(static_cast<std::uint8_t>(big_endian ? value : value >> 8));
+    }
+    ImageView image = view("mono16", static_cast<int>(values.size()), 1, bytes);
+    image.big_endian = big_endian;
+    const auto rgb = color_from_image(image);
+    EXPECT_TRUE(rgb.ok());
+    std::vector<int> out;
+    for (std::size_t i = 0; rgb.ok() && i < rgb->size(); i += 3) out.push_back((*rgb)[i]);
+    return out;
+  };
+  EXPECT_EQ(greys({0, 4, 512, 1020}, false), (std::vector<int>{0, 1, 128, 255}));
+  EXPECT_EQ(greys({0, 4, 512, 1020}, true), (std::vector<int>{0, 1, 128, 255}));
+  EXPECT_EQ(greys({256, 32768, 65280}, false), (std::vector<int>{1, 128, 255}));
+  EXPECT_EQ(greys({0, 9, 255}, false), (std::vector<int>{0, 9, 255}));
+}
 
 TEST(ColorErrors, NamesTheEncodingsItKnows) {
   const std::vector<std::uint8_t> bytes(6);
