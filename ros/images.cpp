@@ -6,6 +6,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <type_traits>
 
 #include <opencv2/imgproc.hpp>
 
@@ -43,21 +44,22 @@ Raw read(const std::uint8_t* bytes, bool swap) {
   return std::bit_cast<Raw>(copy);
 }
 
-template <class Raw, class ToMetres>
-Result<std::vector<float>> read_depth(const ImageView& image, ToMetres to_metres) {
+/// Of an image of one channel.
+template <class Raw, class Convert, class Pixel = std::invoke_result_t<Convert, Raw>>
+Result<std::vector<Pixel>> read_pixels(const ImageView& image, Convert convert) {
   const Result<std::size_t> step = checked_step(image, sizeof(Raw));
   if (!step.ok()) return step.status();
-  std::vector<float> depth;
-  depth.reserve(std::size_t{image.width} * image.height);
+  std::vector<Pixel> pixels;
+  pixels.reserve(std::size_t{image.width} * image.height);
   for (std::size_t v = 0; v < image.height; ++v) {
     const std::uint8_t* row = image.data + v * *step;
-    depth.resize((v + 1) * image.width);  // row by row: what resize writes is still in the cache
-    float* out = depth.data() + v * image.width;
+    pixels.resize((v + 1) * image.width);  // row by row: what resize writes is still in the cache
+    Pixel* out = pixels.data() + v * image.width;
     for (std::size_t u = 0; u < image.width; ++u) {
-      out[u] = to_metres(read<Raw>(row + u * sizeof(Raw), image.big_endian));
+      out[u] = convert(read<Raw>(row + u * sizeof(Raw), image.big_endian));
     }
   }
-  return depth;
+  return pixels;
 }
 
 struct ColorLayout {
@@ -70,21 +72,7 @@ constexpr ColorLayout kColorLayouts[] = {{"rgb8", CV_8UC3, -1},
                                          {"bgr8", CV_8UC3, cv::COLOR_BGR2RGB},
                                          {"rgba8", CV_8UC4, cv::COLOR_RGBA2RGB},
                                          {"bgra8", CV_8UC4, cv::COLOR_BGRA2RGB},
-                                         {"mono8", CV_8UC1, cv::COLOR_GRAY2RGB},
-                                         {"mono16", CV_16UC1, cv::COLOR_GRAY2RGB}};
-
-/// Of a grey image of 10 to 16 bits, the highest eight that its brightest pixel has.
-cv::Mat eight_bits(const cv::Mat& grey, bool big_endian) {
-  cv::Mat bytes[2], out;
-  cv::split(cv::Mat(grey.size(), CV_8UC2, grey.data, grey.step), bytes);
-  if (big_endian) std::swap(bytes[0], bytes[1]);
-  double high = 0;
-  cv::minMaxLoc(bytes[1], nullptr, &high);
-  if (high == 0) return bytes[0];
-  const int shift = std::bit_width(static_cast<unsigned>(high));  // of 256 to 65535
-  cv::addWeighted(bytes[1], std::ldexp(1, 8 - shift), bytes[0], std::ldexp(1, -shift), 0, out);
-  return out;
-}
+                                         {"mono8", CV_8UC1, cv::COLOR_GRAY2RGB}};
 
 }  // namespace
 
@@ -97,24 +85,28 @@ Status check_size(const std::string& what, std::uint32_t width, std::uint32_t he
 
 Result<std::vector<float>> depth_from_image(const ImageView& image) {
   if (image.encoding == "16UC1" || image.encoding == "mono16") {
-    return read_depth<std::uint16_t>(
+    return read_pixels<std::uint16_t>(
         image, [](std::uint16_t mm) { return static_cast<float>(mm * 0.001); });
   }
   if (image.encoding == "32FC1") {
-    return read_depth<float>(image, [](float z) { return z > 0 && std::isfinite(z) ? z : 0.0f; });
+    return read_pixels<float>(image, [](float z) { return z > 0 && std::isfinite(z) ? z : 0.0f; });
   }
   return Status(StatusCode::unsupported, concat(image.field, " encoding is \"", image.encoding,
                                                 "\"; it must be 16UC1 (mm) or 32FC1 (m)"));
 }
 
 Result<std::vector<std::uint8_t>> color_from_image(const ImageView& image) {
+  if (image.encoding == "mono16") {
+    const auto grey = read_pixels<std::uint16_t>(image, [](std::uint16_t value) { return value; });
+    if (!grey.ok()) return grey.status();
+    return io::rgb_of_grey(*grey);
+  }
   for (const ColorLayout& layout : kColorLayouts) {
     if (image.encoding != layout.encoding) continue;
     const Result<std::size_t> step = checked_step(image, CV_ELEM_SIZE(layout.type));
     if (!step.ok()) return step.status();
     const cv::Size size(static_cast<int>(image.width), static_cast<int>(image.height));
-    cv::Mat pixels(size, layout.type, const_cast<std::uint8_t*>(image.data), *step);
-    if (pixels.depth() == CV_16U) pixels = eight_bits(pixels, image.big_endian);
+    const cv::Mat pixels(size, layout.type, const_cast<std::uint8_t*>(image.data), *step);
     std::vector<std::uint8_t> rgb(std::size_t{3} * image.width * image.height);
     cv::Mat out(size, CV_8UC3, rgb.data());
     if (layout.to_rgb < 0) {

@@ -9,7 +9,6 @@
 #include "core/base/concat.hpp"
 #include "core/base/stopwatch.hpp"
 #include "core/cloud/frame_fusion.hpp"
-#include "core/doctor/frame_check.hpp"
 #include "core/doctor/result_check.hpp"
 #include "core/draw/annotate.hpp"
 #include "core/draw/sheet.hpp"
@@ -182,7 +181,7 @@ class DetectRun {
     if (a_.follow) request_.expected = expected_after(scene);
     results_.push_back(reported(scene, input.reported_from_camera, entry, watch.seconds()));
     print_result(input.name, results_.back());
-    if (doctor::says_little(scene)) print_advice(input.frame);
+    print_advice(input.frame, scene);
     std::fflush(stdout);
     const std::string file = io::bop_number(entry.scene_id) + "_" + io::bop_number(entry.im_id);
     if (explain_) {
@@ -202,10 +201,9 @@ class DetectRun {
   }
 
   /// What is wrong with a frame; the same as of another one is not said again.
-  void print_advice(const Frame& frame) {
+  void print_advice(const Frame& frame, const SceneInterpretations& scene) {
     const double range = detector_.options().surface.max_range_m;
-    const std::string advice =
-        doctor::lines_of(doctor::check_frame(frame, range, a_.common.threads));
+    const std::string advice = doctor::advice_on(frame, scene, range, a_.common.threads);
     if (advice.empty() || std::exchange(advice_, advice) == advice) return;
     std::istringstream lines(advice);
     for (std::string line; std::getline(lines, line);) std::printf("  %s\n", line.c_str());

@@ -25,8 +25,9 @@ std::string lines_of(Findings findings) {
   return lines;
 }
 
-std::string advice_on(const Frame& frame, const SceneInterpretations& result, double max_range_m) {
-  return says_little(result) ? lines_of(check_frame(frame, max_range_m, 1)) : "";
+std::string advice_on(const Frame& frame, const SceneInterpretations& result, double max_range_m,
+                      int num_threads) {
+  return says_little(result) ? lines_of(check_frame(frame, max_range_m, num_threads)) : "";
 }
 
 }  // namespace bpa::doctor

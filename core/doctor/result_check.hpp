@@ -17,6 +17,7 @@ bool says_little(const SceneInterpretations& result);
 std::string lines_of(Findings findings);
 
 /// What check_frame() finds in a frame whose result says little, as lines; else empty.
-std::string advice_on(const Frame& frame, const SceneInterpretations& result, double max_range_m);
+std::string advice_on(const Frame& frame, const SceneInterpretations& result, double max_range_m,
+                      int num_threads = 1);
 
 }  // namespace bpa::doctor

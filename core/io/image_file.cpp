@@ -216,11 +216,7 @@ Result<ColorImage> decode_color(const std::string& path, std::string_view bytes,
     std::vector<std::uint16_t> grey;
     Status status = decode_png(path, bytes, *size, PNG_FORMAT_LINEAR_Y, grey);
     if (!status.ok()) return status;
-    // Cameras have 10 to 16 bits.
-    const int shift = std::max(0, std::bit_width(*std::ranges::max_element(grey)) - 8);
-    for (const std::uint16_t value : grey) {
-      image.pixels.insert(image.pixels.end(), 3, static_cast<std::uint8_t>(value >> shift));
-    }
+    image.pixels = rgb_of_grey(grey);
     return image;
   }
   const bool alpha = size->channels == 2 || size->channels == 4;
@@ -327,6 +323,17 @@ Result<ImageSize> read_png_size(const std::string& path) {
   char head[33];
   in.read(head, sizeof head);
   return parse_png_header(path, {head, static_cast<std::size_t>(in.gcount())});
+}
+
+std::vector<std::uint8_t> rgb_of_grey(std::span<const std::uint16_t> grey) {
+  std::vector<std::uint8_t> rgb;
+  if (grey.empty()) return rgb;
+  const int shift = std::max(0, std::bit_width(*std::ranges::max_element(grey)) - 8);
+  rgb.reserve(3 * grey.size());
+  for (const std::uint16_t value : grey) {
+    rgb.insert(rgb.end(), 3, static_cast<std::uint8_t>(value >> shift));
+  }
+  return rgb;
 }
 
 Result<ColorImage> read_color_image(const std::string& path) {

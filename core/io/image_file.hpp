@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -49,6 +50,9 @@ struct ImageSize {
 /// message names the file), invalid_argument (wrong kind of image, or too large) or unsupported
 /// (another format, or a JPEG of more than 32 scans).
 Result<ColorImage> read_color_image(const std::string& path);
+
+/// Grey of cameras of 10 to 16 bits as rgb: the highest eight bits that its largest value has.
+std::vector<std::uint8_t> rgb_of_grey(std::span<const std::uint16_t> grey);
 /// The same of an image in memory, of at most `max_pixels`; `name` is for
 /// messages.
 Result<ColorImage> decode_color_image(std::string_view bytes, const std::string& name,

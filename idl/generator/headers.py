@@ -55,26 +55,24 @@ def headers(structs):
 
 
 def descriptions_header(structs):
-    text = HEAD.format(source='all .idl files') + '#include "idl/wire/field.hpp"\n'
-    text += '\nnamespace bpa::wire {\n\n'
-    text += '/// All types that have a type hash.\n'
-    text += 'inline constexpr TypeDescriptionText kTypeDescriptions[] = {\n'
-    for struct in structs.values():
-        description = json.dumps(full_description(struct, structs, with_defaults=True))
-        text += f'  {{"{struct.name}",\n   "{type_hash(struct, structs)}",\n'
-        text += f'   {raw(description)},\n   {raw(struct.source)}}},\n'
-    return text + '};\n\n}  // namespace bpa::wire\n'
+    return table('All types that have a type hash.', 'TypeDescriptionText kTypeDescriptions', {
+        struct.name: [json.dumps(full_description(struct, structs, with_defaults=True)), struct.source]
+        for struct in structs.values()}, structs)
 
 
 def definitions_header(structs):
+    return table('All types of messages.', 'MessageDefinition kMessageDefinitions', {
+        struct.name: [definition(struct, structs)]
+        for struct in structs.values() if '/msg/' in struct.name}, structs)
+
+
+def table(comment, array, texts, structs):
+    """A header with an array of name, type hash and texts of each struct."""
     text = HEAD.format(source='all .idl files') + '#include "idl/wire/field.hpp"\n'
-    text += '\nnamespace bpa::wire {\n\n'
-    text += '/// All types of messages.\n'
-    text += 'inline constexpr MessageDefinition kMessageDefinitions[] = {\n'
-    for struct in structs.values():
-        if '/msg/' in struct.name:
-            text += (f'  {{"{struct.name}",\n   "{type_hash(struct, structs)}",\n'
-                     f'   {raw(definition(struct, structs))}}},\n')
+    text += f'\nnamespace bpa::wire {{\n\n/// {comment}\ninline constexpr {array}[] = {{\n'
+    for name, row in texts.items():
+        text += f'  {{"{name}",\n   "{type_hash(structs[name], structs)}",\n'
+        text += '   ' + ',\n   '.join(map(raw, row)) + '},\n'
     return text + '};\n\n}  // namespace bpa::wire\n'
 
 

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <random>
 
+#include "client/cli/convert.hpp"
 #include "tests/support/stub_server.hpp"
 #include "tests/support/wall_messages.hpp"
 
@@ -50,19 +51,6 @@ wire::sensor_msgs::CameraInfo camera_info(const Frame& frame) {
   info.r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   info.p = {c.fx, 0, c.cx, 0, 0, c.fy, c.cy, 0, 0, 0, 1, 0};
   return info;
-}
-
-FrameView view_of(const Frame& frame) {
-  FrameView view;
-  view.width = frame.camera.width;
-  view.height = frame.camera.height;
-  view.rgb = frame.color.data();
-  view.depth_m = frame.depth.data();
-  view.fx = frame.camera.fx;
-  view.fy = frame.camera.fy;
-  view.cx = frame.camera.cx;
-  view.cy = frame.camera.cy;
-  return view;
 }
 
 template <class T>
@@ -119,7 +107,7 @@ void RequestLoad::run(const std::vector<Frame>& frames, const std::atomic<bool>&
   while (!stop) {
     const auto start = std::chrono::steady_clock::now();
     const Frame& own = frames[asked % frames.size()];
-    const auto found = asked++ % 2 == 0 ? client.detect() : client.detect_in(view_of(own));
+    const auto found = asked++ % 2 == 0 ? client.detect() : client.detect_in(cli::view_of(own));
     const std::chrono::duration<double, std::milli> took = std::chrono::steady_clock::now() - start;
     if (found.ok()) {
       ++answered;

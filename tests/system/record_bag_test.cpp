@@ -9,6 +9,7 @@
 #include <signal.h>
 #include <yaml-cpp/yaml.h>
 
+#include "client/cli/convert.hpp"
 #include "core/io/bop_dataset.hpp"
 #include "core/io/mesh_file.hpp"
 #include "idl/wire/publisher.hpp"
@@ -17,6 +18,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/wall_bag.hpp"
 #include "tests/system/cli/box_scene.hpp"
+#include "tests/system/cli/camera_messages.hpp"
 
 // bpa-client record --bag as a process, beside the stub server and publishers of this process.
 
@@ -116,15 +118,7 @@ class RecordBag : public testing::Test {
 };
 
 FrameView view_of_frame(const Frame& frame, std::int64_t stamp_ns) {
-  FrameView view;
-  view.width = frame.camera.width;
-  view.height = frame.camera.height;
-  view.rgb = frame.color.data();
-  view.depth_m = frame.depth.data();
-  view.fx = frame.camera.fx;
-  view.fy = frame.camera.fy;
-  view.cx = frame.camera.cx;
-  view.cy = frame.camera.cy;
+  FrameView view = cli::view_of(frame);
   view.stamp_ns = stamp_ns;
   view.frame_id = "optical";
   return view;
@@ -165,23 +159,8 @@ TEST_F(RecordBag, HoldsWhatWasPublished) {
   }
   std::this_thread::sleep_for(milliseconds(500));  // until it hears the server and us
 
-  wire::sensor_msgs::CameraInfo info_message;
-  info_message.header = {wire::builtin_interfaces::from_ns(3 * kSecond + 7), "optical"};
-  info_message.width = static_cast<std::uint32_t>(frame.camera.width);
-  info_message.height = static_cast<std::uint32_t>(frame.camera.height);
-  info_message.k = {
-      frame.camera.fx, 0, frame.camera.cx, 0, frame.camera.fy, frame.camera.cy, 0, 0, 1};
-  wire::sensor_msgs::Image depth_message;
-  depth_message.header = info_message.header;
-  depth_message.width = info_message.width;
-  depth_message.height = info_message.height;
-  depth_message.encoding = "32FC1";
-  depth_message.step = 4 * info_message.width;
-  depth_message.data = support::as_bytes(frame.depth);
-  wire::sensor_msgs::Image color_message = depth_message;
-  color_message.encoding = "rgb8";
-  color_message.step = 3 * info_message.width;
-  color_message.data = frame.color;
+  const auto& [info_message, depth_message, color_message] =
+      test::CameraMessages(frame, 3 * kSecond + 7);
   wire::sensor_msgs::CompressedImage jpeg_message{depth_message.header, "rgb8; jpeg", {1, 2, 255}};
   wire::sensor_msgs::PointCloud2 cloud_message;
   cloud_message.header = depth_message.header;

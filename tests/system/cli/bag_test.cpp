@@ -13,6 +13,7 @@
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/wall_messages.hpp"
 #include "tests/system/cli/box_scene.hpp"
+#include "tests/system/cli/camera_messages.hpp"
 
 namespace bpa {
 namespace {
@@ -25,26 +26,10 @@ void record(std::vector<support::RecordedMessage>& bag, const std::string& topic
 }
 
 void record(std::vector<support::RecordedMessage>& bag, const Frame& frame, std::int64_t stamp_ns) {
-  wire::sensor_msgs::CameraInfo info;
-  info.header = {wire::builtin_interfaces::from_ns(stamp_ns), "optical"};
-  info.width = static_cast<std::uint32_t>(frame.camera.width);
-  info.height = static_cast<std::uint32_t>(frame.camera.height);
-  info.k = {frame.camera.fx, 0, frame.camera.cx, 0, frame.camera.fy, frame.camera.cy, 0, 0, 1};
-  wire::sensor_msgs::Image depth;
-  depth.header = info.header;
-  depth.width = info.width;
-  depth.height = info.height;
-  depth.encoding = "32FC1";
-  depth.step = 4 * info.width;
-  depth.data = support::as_bytes(frame.depth);
-  record(bag, "/camera/camera_info", info);
-  record(bag, "/camera/depth", depth);
-  if (frame.color.empty()) return;
-  wire::sensor_msgs::Image color = depth;
-  color.encoding = "rgb8";
-  color.step = 3 * info.width;
-  color.data = frame.color;
-  record(bag, "/camera/color", color);
+  const test::CameraMessages messages(frame, stamp_ns);
+  record(bag, "/camera/camera_info", messages.info);
+  record(bag, "/camera/depth", messages.depth);
+  if (!frame.color.empty()) record(bag, "/camera/color", messages.color);
 }
 
 TEST(DetectBag, FindsWhatTheFramesShow) {
