@@ -4,7 +4,6 @@
 
 #include <utility>
 
-#include "core/doctor/frame_check.hpp"
 #include "core/doctor/result_check.hpp"
 
 namespace bpa::server {
@@ -12,16 +11,24 @@ namespace bpa::server {
 std::string Advice::on(const Frame& frame, const SceneInterpretations& result, double max_range_m) {
   constexpr auto kAgainAfter = std::chrono::seconds(10);
   if (!doctor::says_little(result)) return {};
-  const std::lock_guard<std::mutex> lock(mutex_);
+  std::unique_lock<std::mutex> lock(mutex_);
   const auto now = std::chrono::steady_clock::now();
   if (now - asked_ >= kAgainAfter || asked_.time_since_epoch().count() == 0) {
     asked_ = now;
+    lock.unlock();
+    const std::string says = doctor::advice_on(frame, result, max_range_m);
+    lock.lock();
     camera_ = frame.frame_id;
-    const std::string says = doctor::lines_of(doctor::check_frame(frame, max_range_m, 1));
     if (std::exchange(said_, says) != says && !says.empty()) {
       log(log_, LogLevel::warning, "little is found in frames of " + camera_ + ": " + says);
     }
   }
+  return camera_ == frame.frame_id ? said_ : "";
+}
+
+std::string Advice::known(const Frame& frame, const SceneInterpretations& result) const {
+  if (!doctor::says_little(result)) return {};
+  const std::lock_guard<std::mutex> lock(mutex_);
   return camera_ == frame.frame_id ? said_ : "";
 }
 

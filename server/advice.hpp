@@ -20,10 +20,12 @@ class Advice {
   /// What is wrong with the frame of a result that says little; else empty. The doctor is asked
   /// once in 10 s; what he did not say before is logged.
   std::string on(const Frame& frame, const SceneInterpretations& result, double max_range_m);
+  /// The same without asking him, which takes as long as a search: what he said before.
+  std::string known(const Frame& frame, const SceneInterpretations& result) const;
 
  private:
   const LogHook log_;
-  std::mutex mutex_;
+  mutable std::mutex mutex_;
   std::string said_, camera_;  ///< The last time, of a frame of that frame_id.
   std::chrono::steady_clock::time_point asked_;
 };

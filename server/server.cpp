@@ -320,6 +320,7 @@ class Running : public Server {
             recognition_,
             *queue_,
             statistics_,
+            advice_,
             [this] {
               statistics_.forget_timings();
               publisher_->publish_vision_info();
@@ -367,15 +368,14 @@ class Running : public Server {
     const int models = static_cast<int>(recognition_->models().size());
     const auto settings = settings_.get();
     const bool of_one_view = result.ok() && frame != nullptr;  // else in the fixed frame
-    const std::string advice =
-        of_one_view ? advice_.on(*frame, *result, settings->detector.surface.max_range_m) : "";
-    publisher_->publish(
-        frame, result,
-        {incoming.stamp_ns, incoming.frame_id, models, settings->detection.seed, advice});
+    publisher_->publish(frame, result,
+                        {incoming.stamp_ns, incoming.frame_id, models, settings->detection.seed,
+                         of_one_view ? advice_.known(*frame, *result) : ""});
     if (!result.ok()) return log_failure(result.status());
     if (of_one_view) {
       tracking_->add(*result);
-      feed_.add_result(*frame, *result, advice);
+      const double range = settings->detector.surface.max_range_m;
+      feed_.add_result(*frame, *result, advice_.on(*frame, *result, range));
     }
     const auto& found = result->interpretations;
     log(log_, LogLevel::debug,

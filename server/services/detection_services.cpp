@@ -7,7 +7,6 @@
 
 #include "core/base/concat.hpp"
 #include "core/base/guarded.hpp"
-#include "core/doctor/result_check.hpp"
 #include "ros/frames.hpp"
 #include "server/convert/results.hpp"
 #include "server/services/requests.hpp"
@@ -72,7 +71,7 @@ msgs::Detect_Response answer_of(const ServiceContext& context, const DetectJob& 
   const double range = context.settings.get()->detector.surface.max_range_m;
   response.result = interpretations_message(
       result, {frame->stamp_ns, frame->frame_id, static_cast<int>(models), job.request.seed,
-               result.ok() ? doctor::advice_on(*frame, *result, range) : ""});
+               result.ok() ? context.advice.on(*frame, *result, range) : ""});
   return response;
 }
 

@@ -12,6 +12,7 @@
 #include "core/base/status.hpp"
 #include "idl/wire/endpoint.hpp"
 #include "idl/wire/msg/bpa_msgs.hpp"
+#include "server/advice.hpp"
 #include "server/recognition.hpp"
 #include "server/search_queue.hpp"
 #include "server/settings.hpp"
@@ -27,6 +28,7 @@ struct ServiceContext {
   std::shared_ptr<Recognition> recognition;
   SearchQueue& queue;
   Statistics& statistics;
+  Advice& advice;
   /// To be called after a model came or went.
   std::function<void()> library_changed;
   LogHook log;
